@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+/// Recorded logs. They are not in the repository: where they are missing, each test is skipped, and ./scanloom lists
+/// it.
 namespace scanloom {
 namespace {
 
@@ -18,19 +20,21 @@ struct Recording {
 
 void PrintTo(const Recording& recording, std::ostream* out) { *out << recording.file; }
 
-std::filesystem::path path_of(const Recording& recording) {
-    return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / recording.file;
+std::filesystem::path path_of(const char* file) {
+    return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / file;
 }
 
 class RealLogs : public testing::TestWithParam<Recording> {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(path_of(GetParam()))) GTEST_SKIP() << "missing file: " << path_of(GetParam());
+        if (!std::filesystem::exists(path_of(GetParam().file)))
+            GTEST_SKIP() << "missing file: " << path_of(GetParam().file);
     }
 
     robot::WholeLog read(robot::NoReturn no_return) {
-        auto log = robot::read_whole_log(path_of(GetParam()), {.no_return = no_return, .range_max = {}, .limits = {}},
-                                         [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
+        auto log =
+            robot::read_whole_log(path_of(GetParam().file), {.no_return = no_return, .range_max = {}, .limits = {}},
+                                  [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
         EXPECT_TRUE(log) << log.error().message;
         return log ? std::move(*log) : robot::WholeLog{};
     }
@@ -72,8 +76,8 @@ TEST_P(RealLogs, GiveTheMapsOfANaiveImplementation) {
 /// The stamps of this log go back 631 times. Sorted by stamp, the trajectory would be 661 m long, with steps of up to
 /// 0.87 m.
 TEST(IntelLog, HasAPlausibleTrajectory) {
-    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
+    const auto path = path_of("intel.clf.bz2");
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "missing file: " << path;
     const auto log = robot::read_whole_log(path, {}, [](const robot::SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->stamps.steps_back, 631U);
