@@ -1,6 +1,5 @@
 #include "tests/fault/cluster.hpp"
 
-#include "server/store/postgres_connection.hpp"
 #include "tests/fault/readiness.hpp"
 
 #include <fmt/format.h>
@@ -8,13 +7,13 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 namespace scanloom::fault {
 namespace {
 
 namespace fs = std::filesystem;
-namespace postgres = store::postgres;
 using test::PostgresServer;
 
 constexpr std::chrono::seconds kDead{7};                              // a node counts as dead after 5 s
@@ -23,6 +22,18 @@ constexpr std::uint64_t kDatabaseDiskBytes = std::uint64_t{12} << 30; // of a sp
 
 /// Returns the path of the socket in a directory, as PostgreSQL and its clients form it.
 fs::path socket_in(const fs::path& directory) { return directory / ".s.PGSQL.5432"; }
+
+/// Starts a server as a service manager does: again if it ends because the database does not answer in time.
+void start(ServerProcess& server) {
+    constexpr int kTries = 10;
+    for (int tries = 1;; ++tries) {
+        try {
+            return server.start_and_wait();
+        } catch (const std::runtime_error&) {
+            if (tries == kTries || server.last_words().find("does not answer within") == std::string::npos) throw;
+        }
+    }
+}
 
 } // namespace
 
@@ -62,7 +73,7 @@ Cluster::Cluster(const Command& server, std::uint64_t seed) : random_(seed) {
         const std::vector<std::string> options{"--node", fmt::format("node{}", n)};
         nodes_.push_back(
             std::unique_ptr<Node>(new Node{std::move(links), ServerProcess(server, place, options, store)}));
-        nodes_.back()->server.start_and_wait();
+        start(nodes_.back()->server);
     }
 }
 
@@ -80,9 +91,7 @@ bool Cluster::cause(const Fault& fault) {
 
 /// Returns the node with the most sessions.
 Cluster::Node& Cluster::busiest_node() {
-    const auto place = fmt::format("postgresql://scanloom@/db1?host={}", primary().socket());
-    auto connection = postgres::Connection::open(postgres::parse_place(place).value()).value();
-    const auto names = connection
+    const auto names = test::connect(fmt::format("postgresql://scanloom@/db1?host={}", primary().socket()))
                            .run("SELECT n.name FROM scanloom.node n LEFT JOIN scanloom.session s ON s.owner = n.id"
                                 " GROUP BY n.name ORDER BY count(s.id) DESC")
                            .value();
@@ -93,13 +102,13 @@ Cluster::Node& Cluster::busiest_node() {
 void Cluster::kill_node() {
     Node& node = busiest_node();
     node.server.kill_nine();
-    node.server.start_and_wait();
+    start(node.server);
 }
 
 void Cluster::stop_node() {
     Node& node = busiest_node();
     stop(node);
-    node.server.start_and_wait();
+    start(node.server);
 }
 
 /// Stops a server that has recovered from the fault before: one whose store has failed does not exit with 0.
@@ -111,7 +120,7 @@ void Cluster::stop(Node& node) {
 
 void Cluster::restart_servers() {
     for (const auto& node : nodes_) stop(*node);
-    for (const auto& node : nodes_) node->server.start_and_wait();
+    for (const auto& node : nodes_) start(node->server);
 }
 
 void Cluster::pause_node() {
@@ -127,7 +136,7 @@ void Cluster::let_node_die() {
     node.server.signal(SIGSTOP);
     node.server.let_be(kDead);
     node.server.kill_nine();
-    node.server.start_and_wait();
+    start(node.server);
 }
 
 void Cluster::cut_off_to_database() { cut_off(DatabaseLink::Direction::kToDatabase); }
@@ -185,7 +194,7 @@ void Cluster::cut_power() {
     for (const auto& node : nodes_) node->server.kill_nine();
     disk_->mount_again();
     for (const auto& database : databases_) database->start();
-    for (const auto& node : nodes_) node->server.start_and_wait();
+    for (const auto& node : nodes_) start(node->server);
 }
 
 } // namespace scanloom::fault

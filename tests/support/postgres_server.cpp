@@ -1,7 +1,5 @@
 #include "tests/support/postgres_server.hpp"
 
-#include "server/store/postgres_connection.hpp"
-
 #include <fmt/format.h>
 
 #include <poll.h>
@@ -15,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace scanloom::test {
@@ -52,11 +51,6 @@ void run(const fs::path& directory, const std::string& program, std::vector<std:
 
 std::string address_of(const std::string& socket, const std::string& database) {
     return fmt::format("postgresql://scanloom@/{}?host={}", database, socket);
-}
-
-store::postgres::Connection connect_to(const std::string& socket, const std::string& database) {
-    return store::postgres::Connection::open(store::postgres::parse_place(address_of(socket, database)).value())
-        .value();
 }
 
 /// Returns the processes that a process has started, and that still run.
@@ -108,7 +102,20 @@ void make_directory(const fs::path& directory) {
     give_away(directory);
 }
 
+/// Connects to the database that each server has.
+store::postgres::Connection connect_to(const PostgresServer& server) {
+    return connect(address_of(server.socket(), "postgres"));
+}
+
 } // namespace
+
+store::postgres::Connection connect(const std::string& address) {
+    constexpr int kTries = 10;
+    const auto place = store::postgres::parse_place(address).value();
+    auto connection = store::postgres::Connection::open(place);
+    for (int tries = 1; !connection && tries < kTries; ++tries) connection = store::postgres::Connection::open(place);
+    return std::move(connection).value();
+}
 
 /// Returns where directories are made: in memory, if there is room, because PostgreSQL creates a thousand files.
 fs::path PostgresServer::place() {
@@ -147,7 +154,7 @@ void PostgresServer::create() {
     }
     start();
     // Only start() reads the log. The server would wait when the pipe is full.
-    connect_to(socket(), "postgres").run("ALTER ROLE scanloom SET log_min_messages = panic").value();
+    connect_to(*this).run("ALTER ROLE scanloom SET log_min_messages = panic").value();
 }
 
 void PostgresServer::stand_by(const PostgresServer& primary) {
@@ -157,7 +164,7 @@ void PostgresServer::stand_by(const PostgresServer& primary) {
     if (!is_synced_) how.emplace_back("--no-sync");
     run(directory_.path(), "pg_basebackup", how);
     start();
-    auto connection = connect_to(primary.socket(), "postgres");
+    auto connection = connect_to(primary);
     connection.run("ALTER SYSTEM SET synchronous_standby_names = 'standby'").value();
     connection.run("SELECT pg_reload_conf()").value();
     while (connection.run("SELECT FROM pg_stat_replication WHERE sync_state = 'sync'").value().size() == 0) {
@@ -215,7 +222,7 @@ void PostgresServer::kill() {
 
 std::string PostgresServer::new_database() {
     const auto name = fmt::format("db{}", ++databases_);
-    auto connection = connect_to(socket(), "postgres");
+    auto connection = connect_to(*this);
     connection.run(fmt::format("CREATE DATABASE {}", name).c_str(), {}, store::postgres::Connection::kLongTimeout)
         .value();
     return address_of(socket(), name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/store/postgres_connection.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -60,5 +61,9 @@ private:
     int databases_ = 0;
     std::optional<ChildProcess> process_;
 };
+
+/// Connects to a database, and tries again if it answers late, as it does while other programs use all processors.
+/// @param address  as for --store
+[[nodiscard]] store::postgres::Connection connect(const std::string& address);
 
 } // namespace scanloom::test

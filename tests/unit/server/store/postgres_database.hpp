@@ -28,8 +28,7 @@ struct PostgresDatabase {
     }
 
     [[nodiscard]] postgres::Rows run(const std::string& sql) const {
-        auto connection = postgres::Connection::open(postgres::parse_place(address).value()).value();
-        return connection.run(sql.c_str()).value();
+        return test::connect(address).run(sql.c_str()).value();
     }
 
     [[nodiscard]] std::int64_t number(const std::string& sql) const { return run(sql).number(0, 0); }
@@ -50,10 +49,9 @@ struct PostgresDatabase {
 
     /// Ends all connections to the database, as a restart of the server does.
     void end_connections() const {
-        auto connection = postgres::Connection::open(postgres::parse_place(address).value()).value();
         static_cast<void>( // a connection that has just ended by itself is a warning, which counts as a failure
-            connection.run("SELECT pg_terminate_backend(pid, 5000) FROM pg_stat_activity"
-                           " WHERE datname = current_database() AND pid <> pg_backend_pid()"));
+            test::connect(address).run("SELECT pg_terminate_backend(pid, 5000) FROM pg_stat_activity"
+                                       " WHERE datname = current_database() AND pid <> pg_backend_pid()"));
     }
 
     std::string address;

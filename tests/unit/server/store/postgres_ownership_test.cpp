@@ -126,7 +126,7 @@ TEST_F(PostgresOwnershipTest, SessionsOfDeadNodesAreTakenByNodesThatLive) {
     static_cast<void>(
         database_.run("UPDATE scanloom.session SET owner = (SELECT id FROM scanloom.node WHERE name = 'other')"));
     const auto node = database_.number("SELECT id FROM scanloom.node WHERE name = 'a'");
-    auto connection = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
+    auto connection = test::connect(database_.address);
     const auto take = [&](bool is_steady) { return postgres::take(connection, session, {node, is_steady}); };
     EXPECT_THAT(take(true).error().message, HasSubstr("belongs to node other;"));
     static_cast<void>(database_.run("UPDATE scanloom.node SET seen = now() - interval '6 s' WHERE name = 'other'"));

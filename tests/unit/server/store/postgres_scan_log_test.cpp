@@ -99,7 +99,7 @@ TEST_F(PostgresScanLogTest, AReaderThatStopsEarlyLeavesItsConnectionToTheNext) {
         EXPECT_EQ(log->read_checkpoint(session, [&](auto, auto) { return stop; }).error(), stop);
         EXPECT_TRUE(log->read(session, 0, [](auto, auto) { return Visit::kStop; }));
     };
-    auto watching = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
+    auto watching = test::connect(database_.address);
     const auto reader = [&] {
         return watching
             .run("SELECT coalesce(max(pid), 0) FROM pg_stat_activity WHERE datname = current_database()"
@@ -267,11 +267,10 @@ TEST_F(PostgresScanLogTest, AnUnreplicatedDatabaseIsRefusedUnlessAllowed) {
 TEST_F(PostgresScanLogTest, NothingIsWrittenWhileAnotherProgramHasTheStoreAlone) {
     const auto log = open().value();
     const auto session = log->create_session("").value();
-    const auto place = postgres::parse_place(database_.address).value();
     std::optional<postgres::Connection> other;
     do { // until it is faster than the log's own thread
         database_.end_connections();
-        other = postgres::Connection::open(place).value();
+        other = test::connect(database_.address);
     } while (other->run("SELECT pg_try_advisory_lock(hashtext('scanloom'), 1)::int::bigint").value().number(0, 0) == 0);
     const auto refused = append_and_wait(*log, session, 1, {"a"});
     EXPECT_EQ(refused.error().code, Errc::kStoreFailed);
