@@ -135,18 +135,18 @@ run_filtered() {
 
 # Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES, or of the files that all parts depend
 # on, changed. '^e2e_([^l]|l[^i])' matches all browser tests but e2e_live, which is in tier 1.
-readonly files_of_all_parts=(CMakeLists.txt CMakePresets.json cmake tests/CMakeLists.txt)
+readonly files_of_all_parts=(CMakeLists.txt CMakePresets.json cmake)
 readonly parts_of_all=(
-    '^tools[.];common/link common/net core/landmarks core/scan_matching core/slam lab load robot_client/uplink sim tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
-    '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client tests/support'
-    '^robot[.].*Trials(/|$);robot_client/recordings robot_client/spool sim tests/unit/robot_client/recordings tests/unit/robot_client/spool tests/unit/sim tests/readers tests/support'
-    '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration tests/support'
+    '^tools[.];common/link common/net core/landmarks core/scan_matching core/slam lab load robot_client/uplink sim tests/CMakeLists.txt tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
+    '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/CMakeLists.txt tests/fault tests/integration/robot_client tests/support'
+    '^robot[.].*Trials(/|$);robot_client/recordings robot_client/spool sim tests/CMakeLists.txt tests/readers tests/support tests/unit/robot_client/recordings tests/unit/robot_client/spool tests/unit/sim'
+    '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/CMakeLists.txt tests/fault tests/integration tests/support'
     '^e2e_([^l]|l[^i]);common/wire/live.cpp proto/scanloom/v1/live.proto server/auth server/http server/live server/tiles tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
     '^python_client_;common/link common/wire proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;tests/integration/robot_client/python docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;tests/e2e/environment.mjs tests/e2e/programs.mjs server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
-    '^lidar_judges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/lidars robot_client/sources tests/readers tests/support'
+    '^lidar_judges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/lidars robot_client/sources tests/readers tests/support/lidar_emulator.cpp tests/support/lidar_emulators.cpp'
     '^bridges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/foxglove robot_client/ros tests/bridges'
     '^readers$;tests/e2e/environment.mjs tests/e2e/programs.mjs server/exchange server/http server/tiles tests/readers'
     '^package$;docker packages.txt packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom server/app tests/package web/package.json web/package-lock.json'
