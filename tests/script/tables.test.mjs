@@ -16,6 +16,19 @@ test('the files of each part of --all exist', () => {
   for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
 
+test('test WORD and CONTRIBUTING.md know every test program', () => {
+  const text = (name) => readFileSync(join(source, name), 'utf8');
+  const made = [...text('tests/CMakeLists.txt').matchAll(/scanloom_test_program\((\w+)_test\b/g)].map(
+    ([, name]) => name,
+  );
+  const known = [...text('tests/tiers.sh').matchAll(/of_tier\+?=\(([a-z ]+)\)/g)].flatMap(([, names]) =>
+    names.split(' '),
+  );
+  assert.ok(made.length > 5);
+  assert.deepEqual(known.sort(), made.sort());
+  for (const name of made) assert.ok(text('CONTRIBUTING.md').includes(`\`${name}_test\``), name);
+});
+
 test('each setting that a document changes is reset by the next configuration', () => {
   const [base] = JSON.parse(readFileSync(join(source, 'CMakePresets.json'), 'utf8')).configurePresets;
   const texts = ['CONTRIBUTING.md', 'docs/internals/build.md', 'docs/internals/testing.md', 'web/CMakeLists.txt'];
