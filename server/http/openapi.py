@@ -5,6 +5,7 @@ usage: openapi.py openapi.yaml openapi_text.hpp
 """
 
 import json
+import pathlib
 import sys
 
 import yaml
@@ -134,5 +135,6 @@ def expanded(source):
 if __name__ == "__main__":
     with open(sys.argv[1], encoding="utf-8") as file:
         text = json.dumps(expanded(yaml.safe_load(file)), ensure_ascii=False)
-    with open(sys.argv[2], "w", encoding="utf-8") as file:
-        file.write(HEADER.format(text))
+    header, path = HEADER.format(text), pathlib.Path(sys.argv[2])
+    if not path.exists() or path.read_text(encoding="utf-8") != header:  # else nothing is compiled again
+        path.write_text(header, encoding="utf-8")
