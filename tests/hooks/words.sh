@@ -15,7 +15,7 @@ found=$(git -c core.quotePath=false -c diff.noprefix=false -c diff.mnemonicPrefi
             gsub(/ground truth/, "", line)
             for (word in instead)
                 if (match(line, "(^|[^a-z_])" word "([^a-z_]|$)"))
-                    print file ": \"" word "\": write " instead[word] ": " substr($0, 2, 100)
+                    print file ": \"" word "\" (better: " instead[word] "): " substr($0, 2, 100)
         }' tests/hooks/words.txt -)
 [[ -z $found ]] && exit 0
 echo "$found" >&2

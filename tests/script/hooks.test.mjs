@@ -15,6 +15,29 @@ test('the hook refuses a commit outside a repository', () => {
   assert.match(run.stderr, /not a git repository/);
 });
 
+test('the hook refuses a commit whose subject is not one', (t) => {
+  const place = mkdtempSync(join(tmpdir(), 'scanloom-hook-test.'));
+  t.after(() => rmSync(place, { recursive: true, force: true }));
+  const check = (message) => {
+    writeFileSync(join(place, 'message'), message);
+    return spawnSync(join(source, 'tests/hooks/commit-msg'), [join(place, 'message')], { encoding: 'utf8' });
+  };
+  const longest = `store: ${'é'.repeat(65)}`;
+  for (const good of [
+    'store: keep 4 KiB blocks\n\nThis says why.',
+    `# remark\n${longest}`,
+    'README: name it',
+    'Revert "store: a"',
+    'fixup! a',
+  ])
+    assert.equal(check(good).status, 0, good);
+  for (const bad of [`${longest}é`, 'keep 4 KiB blocks', 'store:keep', 'store: keep blocks.']) {
+    const refused = check(bad);
+    assert.equal(refused.status, 1, bad);
+    assert.match(refused.stderr, /is no subject; write the part that changes/);
+  }
+});
+
 test('the hook reports words that are not plain English, in comments and documents', (t) => {
   const copy = mkdtempSync(join(tmpdir(), 'scanloom-hook-test.'));
   t.after(() => rmSync(copy, { recursive: true, force: true }));
@@ -31,7 +54,7 @@ test('the hook reports words that are not plain English, in comments and documen
   assert.equal(check('a.cpp', '#include "woven.hpp"\n// Scans are integrated.\nint woven;\n').status, 0);
   const refused = check('a.cpp', '// Scans are woven.\n');
   assert.equal(refused.status, 1);
-  assert.match(refused.stderr, /^a.cpp: "woven": write integrated, or applied: .*Scans are woven/);
+  assert.match(refused.stderr, /^a.cpp: "woven" \(better: integrated, or applied\): .*Scans are woven/);
   assert.equal(check('a.cpp', '').status, 0);
   for (const name of ['a.md', 'a.yaml']) {
     assert.equal(check(name, 'a session that is asleep\n').status, 1, name);
