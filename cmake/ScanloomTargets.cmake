@@ -61,7 +61,7 @@ function(scanloom_headers kind)
   add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/cmake/headers/empty.cpp)
   target_link_libraries(${name} PRIVATE scanloom_options)
   scanloom_kind(${name} ${kind})
-  # In angle brackets, so that no path of this checkout gets into it, and checkouts share what ccache holds.
+  # In angle brackets, so that no path of this checkout gets into it, and ccache shares it among checkouts.
   target_precompile_headers(${name} PRIVATE <cmake/headers/${kind}.hpp>)
 endfunction()
 

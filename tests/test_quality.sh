@@ -71,7 +71,7 @@ run_mutants() {
         shift
     done
     patches=(tests/mutants/${only:-*}.patch)
-    [[ -f ${patches[0]} ]] || misused "there is no mutant '$only', only $(cd tests/mutants && echo *.patch)"
+    [[ -f ${patches[0]} ]] || misused "tests/mutants has no mutant '$only'"
     git rev-parse --git-dir >/dev/null || fail "mutants cannot list the sources of $PWD"
     mkdir -p "$logs" "$copy"
     copy_sources "$copy"

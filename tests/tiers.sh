@@ -3,7 +3,7 @@
 readonly no_tests=2 failing_tests=3 # exit codes: no test has the name; tests ran and failed
 readonly tests_at_once=$(($(nproc) + 1)) # many wait for a browser or a process
 
-# run_test [[--all | --nightly] [FILTER] | --changed COMMIT | --sanitizers [--core]]
+# run_test [[--all | --nightly] [WORD] | --changed COMMIT | --sanitizers [--core]]
 run_test() {
     local tier=first filter=''
     case ${1:-} in

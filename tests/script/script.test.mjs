@@ -28,6 +28,7 @@ test('--help of every command prints its part of the usage only', () => {
       const result = scanloom(command, ...words);
       assert.equal(result.status, 0, `${command}: ${result.stderr}`);
       assert.deepEqual(commandsIn(result.stdout), [command]);
+      assert.equal(scanloom('help', command).stdout, result.stdout);
       assert.ok(usage.includes(result.stdout.split('\n').slice(2).join('\n')));
     }
   }
@@ -42,7 +43,7 @@ test('the usage has every command that the script knows', () => {
 });
 
 test('an unknown command is refused, with and without --help', () => {
-  for (const words of [['paint'], ['paint', '--help']]) {
+  for (const words of [['paint'], ['paint', '--help'], ['help', 'paint']]) {
     const result = scanloom(...words);
     assert.equal(result.status, 2);
     assert.match(result.stderr, /there is no command 'paint'/);
@@ -54,7 +55,7 @@ test('a build that fails for an external reason reports it', () => {
   assert.equal(disk.status, 1);
   assert.match(
     disk.stderr,
-    /^scanloom: configure \(release\) failed: a disk is full \(that of .* has \d+ MB left\); free space/m,
+    /^scanloom: configure \(release\) failed: a disk is full \(that of .*\/build has \d+ MB left\); free space/m,
   );
   const network = scanloomWith({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
@@ -89,7 +90,7 @@ test('unknown arguments are refused before anything is built', () => {
     [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
     [['flakes', '--count', 'x'], /--count is 'x'; a whole number of at most 9 digits is needed/],
     [['flakes', '--count', '0'], /at least 1 is needed/],
-    [['mutants', 'nonsense'], /there is no mutant 'nonsense'/],
+    [['mutants', 'nonsense'], /tests\/mutants has no mutant 'nonsense'/],
     [['fmt', '--chekc'], /fmt takes no '--chekc'/],
     [['tidy', 'no_such.cpp'], /the file 'no_such.cpp' cannot be read/],
     [['install', 'nonsense'], /packages.txt has no section 'nonsense'/],
