@@ -28,7 +28,7 @@ class RealLogs : public testing::TestWithParam<Recording> {
 protected:
     void SetUp() override {
         if (!std::filesystem::exists(path_of(GetParam().file)))
-            GTEST_SKIP() << "missing file: " << path_of(GetParam().file);
+            GTEST_SKIP() << "the recorded log " << path_of(GetParam().file) << " is not here";
     }
 
     robot::WholeLog read(robot::NoReturn no_return) {
@@ -77,7 +77,7 @@ TEST_P(RealLogs, GiveTheMapsOfANaiveImplementation) {
 /// 0.87 m.
 TEST(IntelLog, HasAPlausibleTrajectory) {
     const auto path = path_of("intel.clf.bz2");
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "missing file: " << path;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log " << path << " is not here";
     const auto log = robot::read_whole_log(path, {}, [](const robot::SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->stamps.steps_back, 631U);

@@ -25,7 +25,7 @@ test('the hook refuses a commit whose subject is not one', (t) => {
   const longest = `store: ${'é'.repeat(65)}`;
   for (const good of [
     'store: keep 4 KiB blocks\n\nThis says why.',
-    `# remark\n${longest}`,
+    `# remark\n\n${longest}`,
     'README: name it',
     'Revert "store: a"',
     'fixup! a',
