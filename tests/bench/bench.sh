@@ -22,7 +22,7 @@ run_bench() {
         *) grep --quiet "$what" tests/bench/{,projection/}*.cpp || no_such_benchmark "$what" ;;
     esac
     (($# <= most)) || misused "bench $what takes no '${*:most+1:1}'"
-    [[ $what != robot && -z ${2:-} ]] || log=$(file_of "${2:-}")
+    [[ $what != robot && $# -lt 2 ]] || log=$(file_of "${2:-}")
     case $what in
         viewer | robot) in_browser "tests/bench/${what}_bench.mjs" ${log:+"$log"} $quick && return ;;
     esac

@@ -16,7 +16,7 @@ sys.path.insert(0, str(CLIENT.parent))
 import scanloom_client  # imported by the tests from here
 
 
-faulthandler.dump_traceback_later(200, exit=True)  # prints the stack of a test that hangs
+faulthandler.dump_traceback_later(500, exit=True)  # prints the stack of a test that hangs
 
 
 class RunningServer:
