@@ -30,7 +30,8 @@ inline std::vector<Fuzzer>& fuzzers() {
     return all;
 }
 
-/// @return true: initializes a variable
+/// Adds a fuzzer to fuzzers().
+/// @return true, so that the initializer of a variable can call it
 inline bool add_fuzzer(Fuzzer fuzzer) {
     fuzzers().push_back(std::move(fuzzer));
     return true;
