@@ -1,66 +1,13 @@
-#include "robot_client/app/options.hpp"
+#include "tests/unit/robot_client/app/options_fixture.hpp"
 
 #include "sim/ground_truth.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 namespace scanloom::robot {
 namespace {
 
 using testing::HasSubstr;
-
-class Options : public testing::Test {
-protected:
-    std::variant<RobotOptions, GroundTruthOptions, InfoOptions, LidarsOptions, Leave>
-    parse(std::vector<std::string> words) {
-        std::vector<const char*> argv{"scanloom-robot"};
-        for (const auto& word : words) argv.push_back(word.c_str());
-        return parse_options(static_cast<int>(argv.size()), argv.data());
-    }
-
-    RobotOptions parsed(const std::vector<std::string>& words) {
-        auto result = parse(words);
-        if (const auto* leave = std::get_if<Leave>(&result)) {
-            ADD_FAILURE() << leave->text;
-            return {};
-        }
-        return std::get<RobotOptions>(result);
-    }
-
-    Leave left(const std::vector<std::string>& words) {
-        auto result = parse(words);
-        if (const auto* leave = std::get_if<Leave>(&result)) return *leave;
-        ADD_FAILURE() << "it keeps retrying";
-        return {};
-    }
-
-    void set(const char* name, const char* value) {
-        setenv(name, value, 1);
-        set_.emplace_back(name);
-    }
-
-    std::string file(std::string_view text) {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        file_ = std::filesystem::path(testing::TempDir()) / fmt::format("scanloom_options_{}.toml", test->name());
-        std::ofstream(file_) << text;
-        return file_.string();
-    }
-
-    void TearDown() override {
-        for (const auto& name : set_) unsetenv(name.c_str());
-        if (!file_.empty()) std::filesystem::remove(file_);
-    }
-
-private:
-    std::vector<std::string> set_;
-    std::filesystem::path file_;
-};
 
 TEST_F(Options, AreAcceptedBeforeAndAfterTheSubcommand) {
     for (const auto& words :
@@ -209,60 +156,6 @@ TEST_F(Options, RecordingsHaveTopicsFramesAndMounts) {
     EXPECT_EQ(recording.ranges.is_beyond_no_return, false);
 }
 
-TEST_F(Options, SectionOfTheSourceMayHoldAnOptionOfTheProgram) {
-    const std::vector<std::string> words{"--config", file("session = \"s\"\nrobot = \"r\"\nposes = \"odometry\"\n"
-                                                          "[ld06]\npose-file = \"p\"\nreopen-for = 5\n"
-                                                          "[replay]\nposes = \"none\"\nspeed = 2\n")};
-    const auto with = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), words.begin(), words.end());
-        return more;
-    };
-    const auto replay = parsed(with({"replay", "f"}));
-    EXPECT_EQ(replay.poses, Poses::kNone) << "the section comes before the rest of the file";
-    EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 2.0);
-    EXPECT_EQ(parsed(with({"replay", "f", "--poses", "map"})).poses, Poses::kMap);
-    EXPECT_EQ(parsed(with({"ld06", "f"})).poses, Poses::kOdometry) << "the section is of another source";
-    set("SCANLOOM_POSES", "map");
-    EXPECT_EQ(parsed(with({"replay", "f"})).poses, Poses::kMap);
-    const auto old = file("session = \"s\"\nrobot = \"r\"\n[ld06]\nposes = \"p.txt\"\n");
-    unsetenv("SCANLOOM_POSES");
-    EXPECT_EQ(std::get<LidarOptions>(parsed({"ld06", "f", "--config", old}).source).pose_file, "p.txt");
-    EXPECT_EQ(parsed({"simulate", "--config", old}).poses, std::nullopt);
-}
-
-TEST_F(Options, FlagOverridesEnvironmentOverridesFile) {
-    const auto path =
-        file("session = \"from_file\"\nrobot = \"r\"\ncell-size = 0.1\n[simulate]\nseed = 5\nworld = \"room\"\n");
-    const std::vector<std::string> words{"simulate", "--config", path};
-    EXPECT_EQ(parsed(words).session, "from_file");
-    EXPECT_EQ(parsed(words).cell_size, 0.1);
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).seed, 5U);
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).world, "room");
-    set("SCANLOOM_SESSION", "from_environment");
-    set("SCANLOOM_CELL_SIZE", "0.2");
-    set("SCANLOOM_SEED", "6");
-    EXPECT_EQ(parsed(words).session, "from_environment");
-    EXPECT_EQ(parsed(words).cell_size, 0.2);
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).seed, 6U);
-    const std::vector<std::string> flags{"simulate",    "--config", path,     "--session", "from_flag",
-                                         "--cell-size", "0.3",      "--seed", "7"};
-    EXPECT_EQ(parsed(flags).session, "from_flag");
-    EXPECT_EQ(parsed(flags).cell_size, 0.3);
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(flags).source).seed, 7U);
-}
-
-TEST_F(Options, EnvironmentNamesTheFileForBothSources) {
-    set("SCANLOOM_CONFIG", file("session = \"s\"\nrobot = \"r\"\n").c_str());
-    set("SCANLOOM_SPEED", "3");
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed({"simulate"}).source).speed, 3.0);
-    EXPECT_EQ(std::get<ReplayOptions>(parsed({"replay", "f"}).source).speed, 3.0);
-}
-
-TEST_F(Options, MissingFileOfTheEnvironmentIsAnError) {
-    set("SCANLOOM_CONFIG", "/nonexistent.toml");
-    EXPECT_EQ(left({"simulate", "--session", "s", "--robot", "r"}).code, kExitUsage);
-}
-
 TEST_F(Options, ServerIsHostAndPort) {
     const auto servers = [&](const std::string& server) {
         return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).servers;
@@ -355,14 +248,6 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
         EXPECT_THAT(leave.text, HasSubstr(hint));
         EXPECT_EQ(std::count(leave.text.begin(), leave.text.end(), '\n'), 1) << leave.text;
     }
-}
-
-TEST_F(Options, SeedsUseTheirFullRangeAlsoInTheFile) {
-    const std::vector<std::string> words{
-        "simulate", "--session", "s", "--robot", "r", "--config", file("[simulate]\nseed = -1\n")};
-    EXPECT_THAT(left(words).text, HasSubstr("--seed"));
-    const auto largest = parsed({"simulate", "--session", "s", "--robot", "r", "--seed", "18446744073709551615"});
-    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
 }
 
 TEST_F(Options, ExplorerMayHaveASpool) {

@@ -14,9 +14,7 @@ using testing::IsEmpty;
 class Batching : public testing::Test {
 protected:
     void begin(std::chrono::milliseconds delay, bool compress = false, bool server_understands = true) {
-        link::ClientProtocolOptions options;
-        options.hello.robot = "r1";
-        options.hello.session = "s1";
+        auto options = client_options();
         options.batch_delay = delay;
         options.batch_bytes_max = 4000;
         options.compress = compress;
@@ -32,11 +30,7 @@ protected:
     }
 
     void add(int count) {
-        for (int i = 0; i < count; ++i) {
-            Observation made{laser_, {}};
-            made.scan.ranges.assign(180, 1000);
-            client_->add(std::move(made), now_);
-        }
+        for (int i = 0; i < count; ++i) client_->add(uniform_scan(laser_), now_);
     }
 
     /// Returns the number of scans of each batch that it sends now.
@@ -54,8 +48,7 @@ protected:
     }
 
     ClientLink::Time now_{1000s};
-    std::shared_ptr<const Sensor> laser_ = std::make_shared<const Sensor>(
-        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 180}, 0.0, 0.0, 10.0});
+    std::shared_ptr<const Sensor> laser_ = half_turn_laser();
     std::optional<ClientLink> client_;
     bool server_understands_ = true;
     int compressed_ = 0;
@@ -119,9 +112,7 @@ TEST_F(Batching, ExpiredDelayWithoutCreditSetsNoDeadline) {
 }
 
 TEST_F(Batching, FullBatchesOnlySendsTheRestAtTheEnd) {
-    link::ClientProtocolOptions options;
-    options.hello.robot = "r1";
-    options.hello.session = "s1";
+    auto options = client_options();
     options.batch_scans_max = 3;
     options.only_full_batches = true;
     client_.emplace(options, now_);
@@ -135,10 +126,7 @@ TEST_F(Batching, FullBatchesOnlySendsTheRestAtTheEnd) {
 }
 
 TEST_F(Batching, ScansQueuedBeforeTheWelcomeFollowTheServersScans) {
-    link::ClientProtocolOptions options;
-    options.hello.robot = "r1";
-    options.hello.session = "s1";
-    client_.emplace(options, now_);
+    client_.emplace(client_options(), now_);
     add(3);
     EXPECT_TRUE(client_->buffer.drop_oldest_unsent());
     connect(40);

@@ -13,6 +13,27 @@
 
 namespace scanloom::robot {
 
+/// Returns the options of the robot `r1` in the session `s1`.
+inline link::ClientProtocolOptions client_options() {
+    link::ClientProtocolOptions options;
+    options.hello.robot = "r1";
+    options.hello.session = "s1";
+    return options;
+}
+
+/// @param range_max In metres.
+inline std::shared_ptr<const Sensor> half_turn_laser(double range_max = 10.0) {
+    return std::make_shared<const Sensor>(
+        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 180}, 0.0, 0.0, range_max});
+}
+
+/// Returns a scan whose ranges are all 1 m.
+inline Observation uniform_scan(std::shared_ptr<const Sensor> sensor, std::size_t beams = 180) {
+    Observation made{std::move(sensor), {}};
+    made.scan.ranges.assign(beams, 1000);
+    return made;
+}
+
 /// A ClientProtocol and its SendBuffer, to which a test is the server. The protocol receives the server's frames in
 /// pieces of at most `piece_bytes` bytes.
 class ClientLink {
