@@ -31,7 +31,7 @@ choose_files() {
     local file
     if (($# == 1)); then
         need fmt # git
-        git rev-parse --git-dir >/dev/null || fail "$1 cannot list the files of $PWD; name the files to check"
+        git rev-parse --git-dir >/dev/null 2>&1 || fail "$1 lists the files of a git clone, and $PWD is none; name the files to check"
         mapfile -t files < <(git -c core.quotePath=false ls-files --cached --others --exclude-standard --deduplicate |
             while read -r file; do [[ ! -f $file ]] || echo "$file"; done)
     fi

@@ -48,7 +48,7 @@ list_core_failures() {
 list_failures() {
     local log=$logs/flakes-$1.log status=0
     ctest --preset "$1" --parallel "$tests_at_once" --no-tests=error "${@:2}" --quiet --output-log "$log" || status=$?
-    ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output"
+    ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output$(explain "$log")"
     ((status == 0)) && return
     cat "$log" >>"$logs/flakes-$1-failed.log"
     failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
@@ -61,18 +61,21 @@ failed_tests() {
 
 # run_mutants [NAME] [--all]: each patch of tests/mutants breaks one place. The tests must fail with it, and pass without.
 run_mutants() {
-    local tier=() only='' patches patch missed=() copy=$PWD/build/mutants
+    local tier=() names=() only patches patch missed=() copy=$PWD/build/mutants
     while (($# > 0)); do
         case $1 in
             --all) tier=(--all) ;;
             -*) misused "mutants takes no '$1'" ;;
-            *) [[ -z $only ]] || misused "mutants takes one name, not also '$1'" && only=$1 ;;
+            *) names+=("$1") ;;
         esac
         shift
     done
+    ((${#names[@]} < 2)) || misused "mutants takes one name, not '${names[*]}'"
+    only=${names[*]}
+    ((${#names[@]} == 0)) || [[ $only =~ ^[a-z0-9_]+$ && -f tests/mutants/$only.patch ]] || misused "tests/mutants has no mutant '$only'"
     patches=(tests/mutants/${only:-*}.patch)
-    [[ -f ${patches[0]} ]] || misused "tests/mutants has no mutant '$only'"
-    git rev-parse --git-dir >/dev/null || fail "mutants cannot list the sources of $PWD"
+    need test # git
+    git rev-parse --git-dir >/dev/null 2>&1 || fail "mutants copies the files of a git clone, and $PWD is none; run it in a clone"
     mkdir -p "$logs" "$copy"
     copy_sources "$copy"
     echo "the tests without a mutant"
@@ -125,6 +128,6 @@ mutant_fails() {
     local log=$PWD/$logs/mutant-$2.log status=0
     (cd "$1" && ./scanloom test "${@:4}" ${3:+"$3"}) >"$log" 2>&1 || status=$?
     ((status == 0 || status == failing_tests)) ||
-        fail "the tests of $2 could not be run; the end of $log: $(tail -n 3 "$log")"
+        fail "the tests of $2 could not be run; the end of $log: $(tail -n 3 "$log")$(explain "$log")"
     ((status == failing_tests))
 }

@@ -15,13 +15,21 @@ run_test() {
             run_changed "${@:2}"
             return
             ;;
-        --all) tier=all && shift ;;
-        --nightly) tier=nightly && shift ;;
     esac
-    if (($# > 0)); then
-        filter=$1
-        (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./+]+$ ]] ||
-            misused "test takes one word that is part of a test's name, not '$*'"
+    local words=()
+    while (($# > 0)); do
+        case $1 in
+            --all) tier=all ;;
+            --nightly) tier=nightly ;;
+            -*) misused "test takes no '$1'" ;;
+            *) words+=("$1") ;;
+        esac
+        shift
+    done
+    if ((${#words[@]} > 0)); then
+        filter=${words[0]}
+        ((${#words[@]} == 1)) && [[ $filter =~ ^[A-Za-z0-9_./+]*[A-Za-z0-9_][A-Za-z0-9_./+]*$ ]] ||
+            misused "test takes one word that is part of a test's name, not '${words[*]}'"
         occurs "$filter" || no_test "$filter" "$tier"
     fi
     if [[ -n $filter ]]; then
@@ -86,11 +94,11 @@ run_ctest() {
         grep --invert-match -e ': Skipped$' -e '^--$' | sort | uniq --count || true)
     [[ -z $skipped ]] || printf 'Tests that were skipped, by reason:\n%s\n' "$skipped"
     ((status != 8)) || tests_failed # ctest's code for failing tests
-    ((status == 0)) || fail "ctest ended with code $status"
+    ((status == 0)) || fail "ctest ended with code $status$(explain /dev/null)"
 }
 
 tests_failed() {
-    echo "scanloom: tests failed; the lines above name them" >&2
+    echo "scanloom: tests failed; the lines above name them$(explain /dev/null)" >&2
     exit "$failing_tests"
 }
 
@@ -158,7 +166,8 @@ readonly parts_of_all=(
 # --all whose files differ from those of that commit. All other programs of --all are compiled. The Trials of core_test, maps_test and the
 # programs that run with sanitizers are left out; most of them have a short form, which runs.
 run_changed() {
-    (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit of this clone, not '$*'"
+    (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null 2>&1 ||
+        misused "test --changed takes a commit of the git clone it runs in, not '$*'"
     local part tests files left_out=('^(core|maps)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"

@@ -72,6 +72,11 @@ test('a build that fails for an external reason reports it', () => {
     installing('Could not get lock /var/lib/dpkg/lock-frontend. It is held by process 7'),
     /install \d+ Debian packages failed: another program installs packages; repeat the command when it has ended/,
   );
+  const offline = 'Temporary failure resolving deb.example.org';
+  assert.match(
+    installing(`Unable to locate package cmake"; echo "W: Failed to fetch http://deb.example.org ${offline}`),
+    /install \d+ Debian packages failed: packages were not downloaded; the network must reach/,
+  );
   assert.match(
     installing('Unable to locate package libboost1.81-dev'),
     /install \d+ Debian packages failed: the package sources of this system lack packages of Debian 12 /,
@@ -85,12 +90,17 @@ test('unknown arguments are refused before anything is built', () => {
     [['test', 'two words'], /test takes one word .*, not 'two words'/],
     [['test', 'a', 'b'], /test takes one word .*, not 'a b'/],
     [['test', '--nightly', 'a', 'b'], /test takes one word .*, not 'a b'/],
-    [['test', '--changed'], /test --changed takes a commit of this clone, not ''/],
-    [['test', '--changed', 'nonsense'], /test --changed takes a commit of this clone, not 'nonsense'/],
+    [['test', 'a', '--all', 'b'], /test takes one word .*, not 'a b'/],
+    [['test', 'a', '--alll'], /test takes no '--alll'/],
+    [['test', '.'], /test takes one word .*, not '\.'/],
+    [['test', '--changed'], /test --changed takes a commit of the git clone it runs in, not ''/],
+    [['test', '--changed', 'nonsense'], /test --changed takes a commit of the git clone it runs in, not 'nonsense'/],
     [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
     [['flakes', '--count', 'x'], /--count is 'x'; a whole number of at most 9 digits is needed/],
     [['flakes', '--count', '0'], /at least 1 is needed/],
     [['mutants', 'nonsense'], /tests\/mutants has no mutant 'nonsense'/],
+    [['mutants', '*'], /tests\/mutants has no mutant '\*'/],
+    [['mutants', ''], /tests\/mutants has no mutant ''/],
     [['fmt', '--chekc'], /fmt takes no '--chekc'/],
     [['tidy', 'no_such.cpp'], /the file 'no_such.cpp' cannot be read/],
     [['install', 'nonsense'], /packages.txt has no section 'nonsense'/],
@@ -112,7 +122,7 @@ test('unknown arguments are refused before anything is built', () => {
     [['fault', 'kill', 'link'], /fault takes \[ROW\] .*, not 'kill link'/],
     [['fault', 'kill', '--count'], /fault takes \[ROW\] .*, not 'kill --count'/],
     [['fuzz', 'a', 'b'], /fuzz takes one target, not also 'b'/],
-    [['mutants', 'a', 'b'], /mutants takes one name, not also 'b'/],
+    [['mutants', 'a', 'b'], /mutants takes one name, not 'a b'/],
     [['pictures', 'a', 'b', 'c', 'd'], /pictures needs a log: /],
   ]) {
     const result = scanloomWith(debian, ...words);
