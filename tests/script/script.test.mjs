@@ -53,6 +53,7 @@ test('an unknown command is refused, with and without --help', () => {
 test('a build that fails for an external reason reports it', () => {
   const disk = scanloomWith({ ...debian, cmake: 'echo "write: No space left on device"; exit 1' }, 'demo');
   assert.equal(disk.status, 1);
+  assert.match(disk.stdout, /^This builds the server, the robot and the viewer, .*\n\.\.\. {3}configure \(release\)\n/);
   assert.match(
     disk.stderr,
     /^scanloom: configure \(release\) failed: a disk is full \(that of .*\/build has \d+ MB left\); free space/m,
