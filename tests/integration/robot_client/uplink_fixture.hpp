@@ -57,6 +57,14 @@ protected:
         return outcome;
     }
 
+    /// Returns the message of a run that gives up after 0.3 s.
+    std::string reason_to_give_up() {
+        auto made = options();
+        made.give_up_after = std::chrono::milliseconds(300);
+        const auto outcome = run(made);
+        return outcome ? "it ended without an error" : outcome.error().message;
+    }
+
     void expect_all_stored_once(std::size_t scans = kScans, std::size_t from_earlier = 0) {
         EXPECT_THAT(server_->faults(), testing::IsEmpty());
         ASSERT_EQ(server_->stored().size(), scans);

@@ -42,14 +42,7 @@ TEST_F(ClientProtocolTest, ScanBeyondTheServersLimitsIsAFinalError) {
 }
 
 TEST_F(ClientProtocolTest, LostAcknowledgedScansAreAFinalError) {
-    welcome();
-    add(10);
-    sent_messages();
-    ASSERT_FALSE(ack(8));
-    client_.protocol.close();
-    client_.protocol.open("host:1", now_);
-    sent_messages();
-    const auto failure = client_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
+    const auto failure = welcomed_after_eight_acks({"a1", 5, {}, kPlenty});
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message, HasSubstr("scans 6 to 8 are no longer in memory"));
@@ -57,14 +50,7 @@ TEST_F(ClientProtocolTest, LostAcknowledgedScansAreAFinalError) {
 }
 
 TEST_F(ClientProtocolTest, RecreatedSessionIsAFinalError) {
-    welcome();
-    add(10);
-    sent_messages();
-    ASSERT_FALSE(ack(8));
-    client_.protocol.close();
-    client_.protocol.open("host:1", now_);
-    sent_messages();
-    const auto failure = client_.receive(wire::Welcome{"b2", 0, {}, kPlenty}, now_);
+    const auto failure = welcomed_after_eight_acks({"b2", 0, {}, kPlenty});
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message, HasSubstr("created again"));

@@ -27,6 +27,18 @@ protected:
         return client_.receive(wire::Ack{durable, durable, credit}, now_);
     }
 
+    /// Returns the error of a link that begins with this welcome after the server acknowledged eight of ten scans.
+    std::optional<wire::LinkError> welcomed_after_eight_acks(const wire::Welcome& again) {
+        welcome();
+        add(10);
+        sent_messages();
+        EXPECT_FALSE(ack(8));
+        client_.protocol.close();
+        client_.protocol.open("host:1", now_);
+        sent_messages();
+        return client_.receive(again, now_);
+    }
+
     /// Returns the messages that it sends now.
     std::vector<wire::Message> sent_messages() {
         std::vector<wire::Message> messages;
